@@ -565,7 +565,7 @@ static uint8_t matty_sum_8_negated_final(uint8_t sum) {
 /* Bytes of buffer for the frame of such a payload. */
 static size_t matty_pc_room(size_t payload) {
     const size_t content = 4U + payload + 1U;
-    return 2U * content;
+    return 2U * content - 2U;
 }
 
 /* Where the content is put, before it is stuffed: at the end of the room. */

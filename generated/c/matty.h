@@ -487,19 +487,19 @@ static inline bool matty_transmitted(struct matty_transmission *frame) {
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_STOP_FRAME_MAX 7U
-#define MATTY_STOP_FRAME_ROOM 10U
+#define MATTY_STOP_FRAME_ROOM 8U
 MATTY_API size_t matty_stop_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_stop_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_RESET_FRAME_MAX 7U
-#define MATTY_RESET_FRAME_ROOM 10U
+#define MATTY_RESET_FRAME_ROOM 8U
 MATTY_API size_t matty_reset_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_reset_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_MODE_FRAME_MAX 8U
-#define MATTY_MODE_FRAME_ROOM 12U
+#define MATTY_MODE_FRAME_ROOM 10U
 MATTY_API size_t matty_mode_frame(const struct matty_mode *message, uint8_t counter, uint8_t *frame,
                                   size_t capacity);
 MATTY_API enum matty_result matty_mode_send(const struct matty_mode *message, uint8_t counter,
@@ -507,7 +507,7 @@ MATTY_API enum matty_result matty_mode_send(const struct matty_mode *message, ui
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_GO_FRAME_MAX 14U
-#define MATTY_GO_FRAME_ROOM 18U
+#define MATTY_GO_FRAME_ROOM 16U
 MATTY_API size_t matty_go_frame(const struct matty_go *message, uint8_t counter, uint8_t *frame,
                                 size_t capacity);
 MATTY_API enum matty_result matty_go_send(const struct matty_go *message, uint8_t counter,
@@ -515,7 +515,7 @@ MATTY_API enum matty_result matty_go_send(const struct matty_go *message, uint8_
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_LIMITS_FRAME_MAX 14U
-#define MATTY_LIMITS_FRAME_ROOM 18U
+#define MATTY_LIMITS_FRAME_ROOM 16U
 MATTY_API size_t matty_limits_frame(const struct matty_limits *message, uint8_t counter,
                                     uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_limits_send(const struct matty_limits *message, uint8_t counter,
@@ -523,7 +523,7 @@ MATTY_API enum matty_result matty_limits_send(const struct matty_limits *message
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_TIMING_FRAME_MAX 14U
-#define MATTY_TIMING_FRAME_ROOM 18U
+#define MATTY_TIMING_FRAME_ROOM 16U
 MATTY_API size_t matty_timing_frame(const struct matty_timing *message, uint8_t counter,
                                     uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_timing_send(const struct matty_timing *message, uint8_t counter,
@@ -531,7 +531,7 @@ MATTY_API enum matty_result matty_timing_send(const struct matty_timing *message
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_GPS_MODE_FRAME_MAX 8U
-#define MATTY_GPS_MODE_FRAME_ROOM 12U
+#define MATTY_GPS_MODE_FRAME_ROOM 10U
 MATTY_API size_t matty_gps_mode_frame(const struct matty_gps_mode *message, uint8_t counter,
                                       uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_gps_mode_send(const struct matty_gps_mode *message,
@@ -539,19 +539,19 @@ MATTY_API enum matty_result matty_gps_mode_send(const struct matty_gps_mode *mes
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_ACK_FRAME_MAX 6U
-#define MATTY_ACK_FRAME_ROOM 10U
+#define MATTY_ACK_FRAME_ROOM 8U
 MATTY_API size_t matty_ack_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_ack_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_NACK_FRAME_MAX 6U
-#define MATTY_NACK_FRAME_ROOM 10U
+#define MATTY_NACK_FRAME_ROOM 8U
 MATTY_API size_t matty_nack_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_nack_send(uint8_t counter, matty_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_STATUS_FRAME_MAX 42U
-#define MATTY_STATUS_FRAME_ROOM 46U
+#define MATTY_STATUS_FRAME_ROOM 44U
 MATTY_API size_t matty_status_frame(const struct matty_status *message, uint8_t counter,
                                     uint8_t *frame, size_t capacity);
 MATTY_API enum matty_result matty_status_send(const struct matty_status *message, uint8_t counter,
@@ -559,7 +559,7 @@ MATTY_API enum matty_result matty_status_send(const struct matty_status *message
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_GPS_FRAME_MAX 249U
-#define MATTY_GPS_FRAME_ROOM 252U
+#define MATTY_GPS_FRAME_ROOM 250U
 MATTY_API size_t matty_gps_frame(const struct matty_gps *message, uint8_t counter, uint8_t *frame,
                                  size_t capacity);
 MATTY_API uint8_t *matty_gps_begin(uint8_t *frame, size_t capacity);

@@ -619,7 +619,7 @@ static inline bool matty_v4_transmitted(struct matty_v4_transmission *frame) {
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_STOP_FRAME_MAX 8U
-#define MATTY_V4_STOP_FRAME_ROOM 12U
+#define MATTY_V4_STOP_FRAME_ROOM 11U
 MATTY_V4_API size_t matty_v4_stop_frame(const struct matty_v4_stop *message, uint8_t counter,
                                         uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_stop_send(const struct matty_v4_stop *message,
@@ -627,14 +627,14 @@ MATTY_V4_API enum matty_v4_result matty_v4_stop_send(const struct matty_v4_stop 
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_RESET_FRAME_MAX 7U
-#define MATTY_V4_RESET_FRAME_ROOM 10U
+#define MATTY_V4_RESET_FRAME_ROOM 9U
 MATTY_V4_API size_t matty_v4_reset_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_reset_send(uint8_t counter, matty_v4_put put,
                                                       void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_MODE_FRAME_MAX 8U
-#define MATTY_V4_MODE_FRAME_ROOM 12U
+#define MATTY_V4_MODE_FRAME_ROOM 11U
 MATTY_V4_API size_t matty_v4_mode_frame(const struct matty_v4_mode *message, uint8_t counter,
                                         uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_mode_send(const struct matty_v4_mode *message,
@@ -642,7 +642,7 @@ MATTY_V4_API enum matty_v4_result matty_v4_mode_send(const struct matty_v4_mode 
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_GO_FRAME_MAX 14U
-#define MATTY_V4_GO_FRAME_ROOM 18U
+#define MATTY_V4_GO_FRAME_ROOM 17U
 MATTY_V4_API size_t matty_v4_go_frame(const struct matty_v4_go *message, uint8_t counter,
                                       uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_go_send(const struct matty_v4_go *message,
@@ -650,7 +650,7 @@ MATTY_V4_API enum matty_v4_result matty_v4_go_send(const struct matty_v4_go *mes
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_LIMITS_FRAME_MAX 14U
-#define MATTY_V4_LIMITS_FRAME_ROOM 18U
+#define MATTY_V4_LIMITS_FRAME_ROOM 17U
 MATTY_V4_API size_t matty_v4_limits_frame(const struct matty_v4_limits *message, uint8_t counter,
                                           uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_limits_send(const struct matty_v4_limits *message,
@@ -659,7 +659,7 @@ MATTY_V4_API enum matty_v4_result matty_v4_limits_send(const struct matty_v4_lim
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_TIMING_FRAME_MAX 14U
-#define MATTY_V4_TIMING_FRAME_ROOM 18U
+#define MATTY_V4_TIMING_FRAME_ROOM 17U
 MATTY_V4_API size_t matty_v4_timing_frame(const struct matty_v4_timing *message, uint8_t counter,
                                           uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_timing_send(const struct matty_v4_timing *message,
@@ -668,7 +668,7 @@ MATTY_V4_API enum matty_v4_result matty_v4_timing_send(const struct matty_v4_tim
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_GPS_MODE_FRAME_MAX 8U
-#define MATTY_V4_GPS_MODE_FRAME_ROOM 12U
+#define MATTY_V4_GPS_MODE_FRAME_ROOM 11U
 MATTY_V4_API size_t matty_v4_gps_mode_frame(const struct matty_v4_gps_mode *message,
                                             uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_send(const struct matty_v4_gps_mode *message,
@@ -677,14 +677,14 @@ MATTY_V4_API enum matty_v4_result matty_v4_gps_mode_send(const struct matty_v4_g
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_VERSION_QUERY_FRAME_MAX 7U
-#define MATTY_V4_VERSION_QUERY_FRAME_ROOM 10U
+#define MATTY_V4_VERSION_QUERY_FRAME_ROOM 9U
 MATTY_V4_API size_t matty_v4_version_query_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_version_query_send(uint8_t counter, matty_v4_put put,
                                                               void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_LED_FRAME_MAX 14U
-#define MATTY_V4_LED_FRAME_ROOM 18U
+#define MATTY_V4_LED_FRAME_ROOM 17U
 MATTY_V4_API size_t matty_v4_led_frame(const struct matty_v4_led *message, uint8_t counter,
                                        uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_led_send(const struct matty_v4_led *message,
@@ -692,19 +692,19 @@ MATTY_V4_API enum matty_v4_result matty_v4_led_send(const struct matty_v4_led *m
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_ACK_FRAME_MAX 6U
-#define MATTY_V4_ACK_FRAME_ROOM 10U
+#define MATTY_V4_ACK_FRAME_ROOM 9U
 MATTY_V4_API size_t matty_v4_ack_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_ack_send(uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_NACK_FRAME_MAX 6U
-#define MATTY_V4_NACK_FRAME_ROOM 10U
+#define MATTY_V4_NACK_FRAME_ROOM 9U
 MATTY_V4_API size_t matty_v4_nack_frame(uint8_t counter, uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_nack_send(uint8_t counter, matty_v4_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_STATUS_FRAME_MAX 54U
-#define MATTY_V4_STATUS_FRAME_ROOM 58U
+#define MATTY_V4_STATUS_FRAME_ROOM 57U
 MATTY_V4_API size_t matty_v4_status_frame(const struct matty_v4_status *message, uint8_t counter,
                                           uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_status_send(const struct matty_v4_status *message,
@@ -713,7 +713,7 @@ MATTY_V4_API enum matty_v4_result matty_v4_status_send(const struct matty_v4_sta
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_GPS_FRAME_MAX 249U
-#define MATTY_V4_GPS_FRAME_ROOM 252U
+#define MATTY_V4_GPS_FRAME_ROOM 251U
 MATTY_V4_API size_t matty_v4_gps_frame(const struct matty_v4_gps *message, uint8_t counter,
                                        uint8_t *frame, size_t capacity);
 MATTY_V4_API uint8_t *matty_v4_gps_begin(uint8_t *frame, size_t capacity);
@@ -723,7 +723,7 @@ MATTY_V4_API enum matty_v4_result matty_v4_gps_send(const struct matty_v4_gps *m
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define MATTY_V4_VERSION_FRAME_MAX 11U
-#define MATTY_V4_VERSION_FRAME_ROOM 14U
+#define MATTY_V4_VERSION_FRAME_ROOM 13U
 MATTY_V4_API size_t matty_v4_version_frame(const struct matty_v4_version *message, uint8_t counter,
                                            uint8_t *frame, size_t capacity);
 MATTY_V4_API enum matty_v4_result matty_v4_version_send(const struct matty_v4_version *message,

@@ -892,14 +892,14 @@ static inline bool rflex_transmitted(struct rflex_transmission *frame) {
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_REQUEST_SYSTEM_STATUS_FRAME_MAX 11U
-#define RFLEX_REQUEST_SYSTEM_STATUS_FRAME_ROOM 23U
+#define RFLEX_REQUEST_SYSTEM_STATUS_FRAME_ROOM 15U
 RFLEX_API size_t rflex_request_system_status_frame(uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_request_system_status_send(uint8_t number, rflex_put put,
                                                              void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_SYSTEM_STATUS_FRAME_MAX 40U
-#define RFLEX_SYSTEM_STATUS_FRAME_ROOM 50U
+#define RFLEX_SYSTEM_STATUS_FRAME_ROOM 42U
 RFLEX_API size_t rflex_system_status_frame(const struct rflex_system_status *message,
                                            uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_system_status_send(const struct rflex_system_status *message,
@@ -907,7 +907,7 @@ RFLEX_API enum rflex_result rflex_system_status_send(const struct rflex_system_s
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_00_FRAME_MAX 16U
-#define RFLEX_MOTOR_00_FRAME_ROOM 26U
+#define RFLEX_MOTOR_00_FRAME_ROOM 18U
 RFLEX_API size_t rflex_motor_00_frame(const struct rflex_motor_00 *message, uint8_t number,
                                       uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_motor_00_send(const struct rflex_motor_00 *message,
@@ -915,7 +915,7 @@ RFLEX_API enum rflex_result rflex_motor_00_send(const struct rflex_motor_00 *mes
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_COMMAND_FRAME_MAX 53U
-#define RFLEX_MOTOR_COMMAND_FRAME_ROOM 65U
+#define RFLEX_MOTOR_COMMAND_FRAME_ROOM 57U
 RFLEX_API size_t rflex_motor_command_frame(const struct rflex_motor_command *message,
                                            uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_motor_command_send(const struct rflex_motor_command *message,
@@ -923,7 +923,7 @@ RFLEX_API enum rflex_result rflex_motor_command_send(const struct rflex_motor_co
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CONFIRM_MOTOR_COMMAND_FRAME_MAX 40U
-#define RFLEX_CONFIRM_MOTOR_COMMAND_FRAME_ROOM 50U
+#define RFLEX_CONFIRM_MOTOR_COMMAND_FRAME_ROOM 42U
 RFLEX_API size_t rflex_confirm_motor_command_frame(
     const struct rflex_confirm_motor_command *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -932,19 +932,19 @@ RFLEX_API enum rflex_result rflex_confirm_motor_command_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_0A_FRAME_MAX 11U
-#define RFLEX_MOTOR_0A_FRAME_ROOM 23U
+#define RFLEX_MOTOR_0A_FRAME_ROOM 15U
 RFLEX_API size_t rflex_motor_0a_frame(uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_motor_0a_send(uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_0C_FRAME_MAX 11U
-#define RFLEX_MOTOR_0C_FRAME_ROOM 23U
+#define RFLEX_MOTOR_0C_FRAME_ROOM 15U
 RFLEX_API size_t rflex_motor_0c_frame(uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_motor_0c_send(uint8_t number, rflex_put put, void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_MOTOR_0C_ANSWER_FRAME_MAX 35U
-#define RFLEX_MOTOR_0C_ANSWER_FRAME_ROOM 47U
+#define RFLEX_MOTOR_0C_ANSWER_FRAME_ROOM 39U
 RFLEX_API size_t rflex_motor_0c_answer_frame(const struct rflex_motor_0c_answer *message,
                                              uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_motor_0c_answer_send(const struct rflex_motor_0c_answer *message,
@@ -952,7 +952,7 @@ RFLEX_API enum rflex_result rflex_motor_0c_answer_send(const struct rflex_motor_
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_READ_MOTOR_FRAME_MAX 88U
-#define RFLEX_READ_MOTOR_FRAME_ROOM 98U
+#define RFLEX_READ_MOTOR_FRAME_ROOM 90U
 RFLEX_API size_t rflex_read_motor_frame(const struct rflex_read_motor *message, uint8_t number,
                                         uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_read_motor_send(const struct rflex_read_motor *message,
@@ -960,7 +960,7 @@ RFLEX_API enum rflex_result rflex_read_motor_send(const struct rflex_read_motor 
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
-#define RFLEX_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
+#define RFLEX_START_STOP_MOTOR_PACKETS_FRAME_ROOM 39U
 RFLEX_API size_t rflex_start_stop_motor_packets_frame(
     const struct rflex_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -970,7 +970,7 @@ RFLEX_API enum rflex_result rflex_start_stop_motor_packets_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
-#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
+#define RFLEX_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_ROOM 39U
 RFLEX_API size_t rflex_confirm_start_stop_motor_packets_frame(
     const struct rflex_confirm_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -980,14 +980,14 @@ RFLEX_API enum rflex_result rflex_confirm_start_stop_motor_packets_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_REQUEST_JOYSTICK_DATA_FRAME_MAX 11U
-#define RFLEX_REQUEST_JOYSTICK_DATA_FRAME_ROOM 23U
+#define RFLEX_REQUEST_JOYSTICK_DATA_FRAME_ROOM 15U
 RFLEX_API size_t rflex_request_joystick_data_frame(uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_request_joystick_data_send(uint8_t number, rflex_put put,
                                                              void *user);
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_JOYSTICK_DATA_FRAME_MAX 52U
-#define RFLEX_JOYSTICK_DATA_FRAME_ROOM 62U
+#define RFLEX_JOYSTICK_DATA_FRAME_ROOM 54U
 RFLEX_API size_t rflex_joystick_data_frame(const struct rflex_joystick_data *message,
                                            uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_joystick_data_send(const struct rflex_joystick_data *message,
@@ -995,7 +995,7 @@ RFLEX_API enum rflex_result rflex_joystick_data_send(const struct rflex_joystick
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_START_STOP_SONAR_PACKETS_FRAME_MAX 52U
-#define RFLEX_START_STOP_SONAR_PACKETS_FRAME_ROOM 62U
+#define RFLEX_START_STOP_SONAR_PACKETS_FRAME_ROOM 54U
 RFLEX_API size_t rflex_start_stop_sonar_packets_frame(
     const struct rflex_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1005,7 +1005,7 @@ RFLEX_API enum rflex_result rflex_start_stop_sonar_packets_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_MAX 35U
-#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_ROOM 47U
+#define RFLEX_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_ROOM 39U
 RFLEX_API size_t rflex_confirm_start_stop_sonar_packets_frame(
     const struct rflex_confirm_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1015,7 +1015,7 @@ RFLEX_API enum rflex_result rflex_confirm_start_stop_sonar_packets_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_SONAR_DATA_FRAME_MAX 773U
-#define RFLEX_SONAR_DATA_FRAME_ROOM 785U
+#define RFLEX_SONAR_DATA_FRAME_ROOM 777U
 RFLEX_API size_t rflex_sonar_data_frame(const struct rflex_sonar_data *message, uint8_t number,
                                         uint8_t *frame, size_t capacity);
 RFLEX_API uint8_t *rflex_sonar_data_begin(uint8_t *frame, size_t capacity);
@@ -1025,7 +1025,7 @@ RFLEX_API enum rflex_result rflex_sonar_data_send(const struct rflex_sonar_data 
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_INITIALIZE_DIGITAL_IO_FRAME_MAX 23U
-#define RFLEX_INITIALIZE_DIGITAL_IO_FRAME_ROOM 35U
+#define RFLEX_INITIALIZE_DIGITAL_IO_FRAME_ROOM 27U
 RFLEX_API size_t rflex_initialize_digital_io_frame(
     const struct rflex_initialize_digital_io *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1034,7 +1034,7 @@ RFLEX_API enum rflex_result rflex_initialize_digital_io_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_MAX 35U
-#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_ROOM 47U
+#define RFLEX_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_ROOM 39U
 RFLEX_API size_t rflex_confirm_initialize_digital_io_frame(
     const struct rflex_confirm_initialize_digital_io *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1044,7 +1044,7 @@ RFLEX_API enum rflex_result rflex_confirm_initialize_digital_io_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CHANGED_BUMPERS_FRAME_MAX 34U
-#define RFLEX_CHANGED_BUMPERS_FRAME_ROOM 44U
+#define RFLEX_CHANGED_BUMPERS_FRAME_ROOM 36U
 RFLEX_API size_t rflex_changed_bumpers_frame(const struct rflex_changed_bumpers *message,
                                              uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_changed_bumpers_send(const struct rflex_changed_bumpers *message,
@@ -1052,7 +1052,7 @@ RFLEX_API enum rflex_result rflex_changed_bumpers_send(const struct rflex_change
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CHECK_IO_CHANGED_FRAME_MAX 23U
-#define RFLEX_CHECK_IO_CHANGED_FRAME_ROOM 35U
+#define RFLEX_CHECK_IO_CHANGED_FRAME_ROOM 27U
 RFLEX_API size_t rflex_check_io_changed_frame(const struct rflex_check_io_changed *message,
                                               uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_check_io_changed_send(
@@ -1060,7 +1060,7 @@ RFLEX_API enum rflex_result rflex_check_io_changed_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CHECK_IO_CHANGED_ANSWER_FRAME_MAX 47U
-#define RFLEX_CHECK_IO_CHANGED_ANSWER_FRAME_ROOM 59U
+#define RFLEX_CHECK_IO_CHANGED_ANSWER_FRAME_ROOM 51U
 RFLEX_API size_t rflex_check_io_changed_answer_frame(
     const struct rflex_check_io_changed_answer *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1069,7 +1069,7 @@ RFLEX_API enum rflex_result rflex_check_io_changed_answer_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_CHANGED_BYTE_FRAME_MAX 34U
-#define RFLEX_CHANGED_BYTE_FRAME_ROOM 44U
+#define RFLEX_CHANGED_BYTE_FRAME_ROOM 36U
 RFLEX_API size_t rflex_changed_byte_frame(const struct rflex_changed_byte *message, uint8_t number,
                                           uint8_t *frame, size_t capacity);
 RFLEX_API enum rflex_result rflex_changed_byte_send(const struct rflex_changed_byte *message,

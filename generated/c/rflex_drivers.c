@@ -1188,7 +1188,7 @@ static uint8_t rflex_drivers_xor_8_final(uint8_t sum) {
 /* Bytes of buffer for the frame of such a payload. */
 static size_t rflex_drivers_linux_room(size_t payload) {
     const size_t content = 6U + payload + 1U;
-    return 3U * content + 2U;
+    return 3U * content - 6U;
 }
 
 /* Where the content is put, before it is stuffed: at the end of the room. */

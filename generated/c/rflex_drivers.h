@@ -1148,7 +1148,7 @@ static inline bool rflex_drivers_transmitted(struct rflex_drivers_transmission *
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_MAX 13U
-#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_ROOM 23U
+#define RFLEX_DRIVERS_REQUEST_SYSTEM_STATUS_FRAME_ROOM 15U
 RFLEX_DRIVERS_API size_t rflex_drivers_request_system_status_frame(uint8_t number, uint8_t *frame,
                                                                    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_system_status_send(
@@ -1156,7 +1156,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_system_status_
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_SYSTEM_STATUS_FRAME_MAX 38U
-#define RFLEX_DRIVERS_SYSTEM_STATUS_FRAME_ROOM 50U
+#define RFLEX_DRIVERS_SYSTEM_STATUS_FRAME_ROOM 42U
 RFLEX_DRIVERS_API size_t rflex_drivers_system_status_frame(
     const struct rflex_drivers_system_status *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1166,7 +1166,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_system_status_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_LCD_DUMP_FRAME_MAX 776U
-#define RFLEX_DRIVERS_LCD_DUMP_FRAME_ROOM 788U
+#define RFLEX_DRIVERS_LCD_DUMP_FRAME_ROOM 780U
 RFLEX_DRIVERS_API size_t rflex_drivers_lcd_dump_frame(const struct rflex_drivers_lcd_dump *message,
                                                       uint8_t number, uint8_t *frame,
                                                       size_t capacity);
@@ -1179,7 +1179,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_lcd_dump_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_AXIS_GET_SYSTEM_FRAME_MAX 14U
-#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_FRAME_ROOM 26U
+#define RFLEX_DRIVERS_AXIS_GET_SYSTEM_FRAME_ROOM 18U
 RFLEX_DRIVERS_API size_t rflex_drivers_axis_get_system_frame(
     const struct rflex_drivers_axis_get_system *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1189,7 +1189,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_axis_get_system_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_MOTOR_COMMAND_FRAME_MAX 53U
-#define RFLEX_DRIVERS_MOTOR_COMMAND_FRAME_ROOM 65U
+#define RFLEX_DRIVERS_MOTOR_COMMAND_FRAME_ROOM 57U
 RFLEX_DRIVERS_API size_t rflex_drivers_motor_command_frame(
     const struct rflex_drivers_motor_command *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1199,7 +1199,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_motor_command_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_FRAME_MAX 38U
-#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_FRAME_ROOM 50U
+#define RFLEX_DRIVERS_CONFIRM_MOTOR_COMMAND_FRAME_ROOM 42U
 RFLEX_DRIVERS_API size_t rflex_drivers_confirm_motor_command_frame(
     const struct rflex_drivers_confirm_motor_command *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1209,7 +1209,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_motor_command_
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_SET_DEFAULTS_FRAME_MAX 11U
-#define RFLEX_DRIVERS_SET_DEFAULTS_FRAME_ROOM 23U
+#define RFLEX_DRIVERS_SET_DEFAULTS_FRAME_ROOM 15U
 RFLEX_DRIVERS_API size_t rflex_drivers_set_defaults_frame(uint8_t number, uint8_t *frame,
                                                           size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_send(uint8_t number,
@@ -1218,7 +1218,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_set_defaults_send(uint
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_BRAKE_SET_FRAME_MAX 11U
-#define RFLEX_DRIVERS_BRAKE_SET_FRAME_ROOM 23U
+#define RFLEX_DRIVERS_BRAKE_SET_FRAME_ROOM 15U
 RFLEX_DRIVERS_API size_t rflex_drivers_brake_set_frame(uint8_t number, uint8_t *frame,
                                                        size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_send(uint8_t number,
@@ -1227,7 +1227,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_set_send(uint8_t
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_BRAKE_RELEASE_FRAME_MAX 11U
-#define RFLEX_DRIVERS_BRAKE_RELEASE_FRAME_ROOM 23U
+#define RFLEX_DRIVERS_BRAKE_RELEASE_FRAME_ROOM 15U
 RFLEX_DRIVERS_API size_t rflex_drivers_brake_release_frame(uint8_t number, uint8_t *frame,
                                                            size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_send(uint8_t number,
@@ -1236,7 +1236,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_send(uin
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_FRAME_MAX 35U
-#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_FRAME_ROOM 47U
+#define RFLEX_DRIVERS_BRAKE_RELEASE_ANSWER_FRAME_ROOM 39U
 RFLEX_DRIVERS_API size_t rflex_drivers_brake_release_answer_frame(
     const struct rflex_drivers_brake_release_answer *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1246,7 +1246,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_brake_release_answer_s
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_READ_MOTOR_FRAME_MAX 86U
-#define RFLEX_DRIVERS_READ_MOTOR_FRAME_ROOM 98U
+#define RFLEX_DRIVERS_READ_MOTOR_FRAME_ROOM 90U
 RFLEX_DRIVERS_API size_t rflex_drivers_read_motor_frame(
     const struct rflex_drivers_read_motor *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1256,7 +1256,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_read_motor_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
-#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
+#define RFLEX_DRIVERS_START_STOP_MOTOR_PACKETS_FRAME_ROOM 39U
 RFLEX_DRIVERS_API size_t rflex_drivers_start_stop_motor_packets_frame(
     const struct rflex_drivers_start_stop_motor_packets *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1266,7 +1266,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_motor_packe
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_MAX 35U
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_ROOM 47U
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_MOTOR_PACKETS_FRAME_ROOM 39U
 RFLEX_DRIVERS_API size_t rflex_drivers_confirm_start_stop_motor_packets_frame(
     const struct rflex_drivers_confirm_start_stop_motor_packets *message, uint8_t number,
     uint8_t *frame, size_t capacity);
@@ -1276,7 +1276,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_mot
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_FRAME_MAX 11U
-#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_FRAME_ROOM 23U
+#define RFLEX_DRIVERS_REQUEST_JOYSTICK_DATA_FRAME_ROOM 15U
 RFLEX_DRIVERS_API size_t rflex_drivers_request_joystick_data_frame(uint8_t number, uint8_t *frame,
                                                                    size_t capacity);
 RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_joystick_data_send(
@@ -1284,7 +1284,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_request_joystick_data_
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_JOYSTICK_DATA_FRAME_MAX 50U
-#define RFLEX_DRIVERS_JOYSTICK_DATA_FRAME_ROOM 62U
+#define RFLEX_DRIVERS_JOYSTICK_DATA_FRAME_ROOM 54U
 RFLEX_DRIVERS_API size_t rflex_drivers_joystick_data_frame(
     const struct rflex_drivers_joystick_data *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1294,7 +1294,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_joystick_data_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_FRAME_MAX 50U
-#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_FRAME_ROOM 62U
+#define RFLEX_DRIVERS_START_STOP_SONAR_PACKETS_FRAME_ROOM 54U
 RFLEX_DRIVERS_API size_t rflex_drivers_start_stop_sonar_packets_frame(
     const struct rflex_drivers_start_stop_sonar_packets *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1304,7 +1304,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_start_stop_sonar_packe
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_MAX 35U
-#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_ROOM 47U
+#define RFLEX_DRIVERS_CONFIRM_START_STOP_SONAR_PACKETS_FRAME_ROOM 39U
 RFLEX_DRIVERS_API size_t rflex_drivers_confirm_start_stop_sonar_packets_frame(
     const struct rflex_drivers_confirm_start_stop_sonar_packets *message, uint8_t number,
     uint8_t *frame, size_t capacity);
@@ -1314,7 +1314,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_start_stop_son
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_SONAR_DATA_FRAME_MAX 773U
-#define RFLEX_DRIVERS_SONAR_DATA_FRAME_ROOM 785U
+#define RFLEX_DRIVERS_SONAR_DATA_FRAME_ROOM 777U
 RFLEX_DRIVERS_API size_t rflex_drivers_sonar_data_frame(
     const struct rflex_drivers_sonar_data *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1327,7 +1327,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_sonar_data_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_FRAME_MAX 23U
-#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_FRAME_ROOM 35U
+#define RFLEX_DRIVERS_INITIALIZE_DIGITAL_IO_FRAME_ROOM 27U
 RFLEX_DRIVERS_API size_t rflex_drivers_initialize_digital_io_frame(
     const struct rflex_drivers_initialize_digital_io *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1337,7 +1337,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_initialize_digital_io_
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_MAX 35U
-#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_ROOM 47U
+#define RFLEX_DRIVERS_CONFIRM_INITIALIZE_DIGITAL_IO_FRAME_ROOM 39U
 RFLEX_DRIVERS_API size_t rflex_drivers_confirm_initialize_digital_io_frame(
     const struct rflex_drivers_confirm_initialize_digital_io *message, uint8_t number,
     uint8_t *frame, size_t capacity);
@@ -1347,7 +1347,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_confirm_initialize_dig
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CHANGED_BUMPERS_FRAME_MAX 32U
-#define RFLEX_DRIVERS_CHANGED_BUMPERS_FRAME_ROOM 44U
+#define RFLEX_DRIVERS_CHANGED_BUMPERS_FRAME_ROOM 36U
 RFLEX_DRIVERS_API size_t rflex_drivers_changed_bumpers_frame(
     const struct rflex_drivers_changed_bumpers *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1357,7 +1357,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_bumpers_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_FRAME_MAX 23U
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_FRAME_ROOM 35U
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_FRAME_ROOM 27U
 RFLEX_DRIVERS_API size_t rflex_drivers_check_io_changed_frame(
     const struct rflex_drivers_check_io_changed *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1367,7 +1367,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_FRAME_MAX 47U
-#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_FRAME_ROOM 59U
+#define RFLEX_DRIVERS_CHECK_IO_CHANGED_ANSWER_FRAME_ROOM 51U
 RFLEX_DRIVERS_API size_t rflex_drivers_check_io_changed_answer_frame(
     const struct rflex_drivers_check_io_changed_answer *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1377,7 +1377,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_check_io_changed_answe
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_CHANGED_BYTE_FRAME_MAX 32U
-#define RFLEX_DRIVERS_CHANGED_BYTE_FRAME_ROOM 44U
+#define RFLEX_DRIVERS_CHANGED_BYTE_FRAME_ROOM 36U
 RFLEX_DRIVERS_API size_t rflex_drivers_changed_byte_frame(
     const struct rflex_drivers_changed_byte *message, uint8_t number, uint8_t *frame,
     size_t capacity);
@@ -1387,7 +1387,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_changed_byte_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_IR_RUN_FRAME_MAX 74U
-#define RFLEX_DRIVERS_IR_RUN_FRAME_ROOM 86U
+#define RFLEX_DRIVERS_IR_RUN_FRAME_ROOM 78U
 RFLEX_DRIVERS_API size_t rflex_drivers_ir_run_frame(const struct rflex_drivers_ir_run *message,
                                                     uint8_t number, uint8_t *frame,
                                                     size_t capacity);
@@ -1396,7 +1396,7 @@ RFLEX_DRIVERS_API enum rflex_drivers_result rflex_drivers_ir_run_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define RFLEX_DRIVERS_IR_REPORT_FRAME_MAX 776U
-#define RFLEX_DRIVERS_IR_REPORT_FRAME_ROOM 788U
+#define RFLEX_DRIVERS_IR_REPORT_FRAME_ROOM 780U
 RFLEX_DRIVERS_API size_t rflex_drivers_ir_report_frame(
     const struct rflex_drivers_ir_report *message, uint8_t number, uint8_t *frame, size_t capacity);
 RFLEX_DRIVERS_API uint8_t *rflex_drivers_ir_report_begin(uint8_t *frame, size_t capacity);

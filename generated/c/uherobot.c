@@ -211,7 +211,7 @@ enum {
 /* Bytes of buffer for the frame of such a payload. */
 static size_t uherobot_daemon_room(size_t payload) {
     const size_t content = 3U + payload;
-    return 2U * content + 1U;
+    return 2U * content;
 }
 
 /* Where the content is put, before it is stuffed: at the end of the room. */

@@ -281,7 +281,7 @@ static inline bool uherobot_transmitted(struct uherobot_transmission *frame) {
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_MOTORS_SERVOS_LEDS_FRAME_MAX 48U
-#define UHEROBOT_MOTORS_SERVOS_LEDS_FRAME_ROOM 49U
+#define UHEROBOT_MOTORS_SERVOS_LEDS_FRAME_ROOM 48U
 UHEROBOT_API size_t uherobot_motors_servos_leds_frame(
     const struct uherobot_motors_servos_leds *message, uint8_t *frame, size_t capacity);
 UHEROBOT_API enum uherobot_result uherobot_motors_servos_leds_send(
@@ -289,7 +289,7 @@ UHEROBOT_API enum uherobot_result uherobot_motors_servos_leds_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_MOTORS_TWO_SERVOS_FRAME_MAX 22U
-#define UHEROBOT_MOTORS_TWO_SERVOS_FRAME_ROOM 23U
+#define UHEROBOT_MOTORS_TWO_SERVOS_FRAME_ROOM 22U
 UHEROBOT_API size_t uherobot_motors_two_servos_frame(
     const struct uherobot_motors_two_servos *message, uint8_t *frame, size_t capacity);
 UHEROBOT_API enum uherobot_result uherobot_motors_two_servos_send(
@@ -297,7 +297,7 @@ UHEROBOT_API enum uherobot_result uherobot_motors_two_servos_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_MOTOR_TEST_FRAME_MAX 14U
-#define UHEROBOT_MOTOR_TEST_FRAME_ROOM 15U
+#define UHEROBOT_MOTOR_TEST_FRAME_ROOM 14U
 UHEROBOT_API size_t uherobot_motor_test_frame(const struct uherobot_motor_test *message,
                                               uint8_t *frame, size_t capacity);
 UHEROBOT_API enum uherobot_result uherobot_motor_test_send(
@@ -305,7 +305,7 @@ UHEROBOT_API enum uherobot_result uherobot_motor_test_send(
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_STATUS_FRAME_MAX 18U
-#define UHEROBOT_STATUS_FRAME_ROOM 19U
+#define UHEROBOT_STATUS_FRAME_ROOM 18U
 UHEROBOT_API size_t uherobot_status_frame(const struct uherobot_status *message, uint8_t *frame,
                                           size_t capacity);
 UHEROBOT_API enum uherobot_result uherobot_status_send(const struct uherobot_status *message,

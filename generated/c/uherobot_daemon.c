@@ -165,7 +165,7 @@ enum {
 /* Bytes of buffer for the frame of such a payload. */
 static size_t uherobot_daemon_daemon_room(size_t payload) {
     const size_t content = 3U + payload;
-    return 2U * content + 1U;
+    return 2U * content;
 }
 
 /* Where the content is put, before it is stuffed: at the end of the room. */
@@ -225,7 +225,7 @@ static size_t uherobot_daemon_daemon_wrap(uint8_t *frame, size_t payload, uint8_
 /* Bytes of buffer for the frame of such a payload. */
 static size_t uherobot_daemon_board_room(size_t payload) {
     const size_t content = 3U + payload;
-    return 2U * content + 2U;
+    return 2U * content + 1U;
 }
 
 /* Where the content is put, before it is stuffed: at the end of the room. */

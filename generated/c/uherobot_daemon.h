@@ -262,7 +262,7 @@ static inline bool uherobot_daemon_transmitted(struct uherobot_daemon_transmissi
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_FRAME_MAX 48U
-#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_FRAME_ROOM 49U
+#define UHEROBOT_DAEMON_MOTORS_SERVOS_LEDS_FRAME_ROOM 48U
 UHEROBOT_DAEMON_API size_t uherobot_daemon_motors_servos_leds_frame(
     const struct uherobot_daemon_motors_servos_leds *message, uint8_t *frame, size_t capacity);
 UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_motors_servos_leds_send(
@@ -270,7 +270,7 @@ UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_motors_servos_le
 
 /** Greatest frame, and the buffer that suffices for every frame, in bytes. */
 #define UHEROBOT_DAEMON_STATUS_FRAME_MAX 31U
-#define UHEROBOT_DAEMON_STATUS_FRAME_ROOM 32U
+#define UHEROBOT_DAEMON_STATUS_FRAME_ROOM 31U
 UHEROBOT_DAEMON_API size_t uherobot_daemon_status_frame(
     const struct uherobot_daemon_status *message, uint8_t *frame, size_t capacity);
 UHEROBOT_DAEMON_API enum uherobot_daemon_result uherobot_daemon_status_send(

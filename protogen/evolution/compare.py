@@ -16,6 +16,7 @@ from protogen.evolution.rules import BY_NAME, Category
 from protogen.evolution.shapes import shape
 from protogen.evolution.tellers import renamed_tellers
 from protogen.model.frame_plan import EndRule, FramePlan
+from protogen.model.frame_room import room
 from protogen.model.identities import Identities
 from protogen.model.messages import Message
 from protogen.model.protocol import Link, Protocol, Sender
@@ -155,7 +156,7 @@ def _obstacle(message: Message, old: FramePlan, new: FramePlan) -> str:
         return ""  # It goes on at the next delimiter, or has no other messages.
     if old.end_rule is EndRule.IDENTITY:
         return "an unknown identity tells no size"
-    greatest = new.room(message.sizes.greatest)
+    greatest = room(new, message.sizes.greatest)
     sizes = new.frame.payload.sent(message.sizes)
     if greatest > old.greatest or not old.payload.holds(sizes):
         return f"frames of up to {greatest} bytes, and old receivers take {old.greatest} at most"

@@ -36,7 +36,6 @@ from protogen.model.parts import (
     written_apart,
 )
 from protogen.model.sizes import SizeSet
-from protogen.model.transparency import FULL_GROUP, Cobs
 
 _FEW = 256
 """So many identities are looked at one by one."""
@@ -194,18 +193,6 @@ class FramePlan(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     def bounds_payload(self) -> bool:
         """True if no frame carries a payload greater than the plan's, whatever its message is."""
         return self.length is not None or self.frame.limit is not None
-
-    def room(self, payload: int) -> int:
-        """Wire bytes that the frame of a payload can need."""
-        absent = 0 if payload else self.optional_size
-        content = self.head_size + payload + self.tail_size - absent
-        if self.region is None:
-            return content + len(self.end_bytes)
-        if isinstance(self.region.encoding, Cobs):
-            return content + len(self.end_bytes) + content // FULL_GROUP + 1
-        if self.region.insertion is not None:
-            return content + len(self.end_bytes) + content // len(self.region.insertion.sequence)
-        return self.region.longest * content + len(self.end_bytes)
 
     def told_size(self, wire: int) -> dict[str, int]:
         """The length that a receiver is told of a frame of so many bytes, if it is told one.

@@ -58,8 +58,8 @@ def less_absent(place: Place, payload: str) -> str:
 
 
 def plus(size: int) -> str:
-    """A size that is added to what stands in front of it."""
-    return f" + {size}U" if size else ""
+    """A size that is added to what stands in front of it, or taken away where it is below 0."""
+    return f" {'-' if size < 0 else '+'} {abs(size)}U" if size else ""
 
 
 # --- bytes ----------------------------------------------------------------------------------------

@@ -7,6 +7,8 @@ from collections.abc import Iterable, Iterator
 
 import msgspec
 
+from protogen.copying import replace
+from protogen.model.frame_room import room_beside
 from protogen.model.protocol import Protocol, Sender
 from protogen.targets.c.decoders.decoder import DecoderView, decoder_view
 from protogen.targets.c.decoders.forms import FormsDecoder, forms_decoders
@@ -59,6 +61,8 @@ class FramingView(msgspec.Struct, frozen=True):
     """Those in which no group of COBS is ever full, so that no byte moves when they are stuffed."""
     around_bytes: frozenset[str]
     """Those in which the payloads of several messages are a byte, so that they share a function."""
+    beside: dict[str, int]
+    """What frames that are stuffed byte by byte need beside the most for each byte of content."""
     around_others: frozenset[str]
     """Those in which that of some message is anything else."""
     trims: frozenset[str]
@@ -149,7 +153,10 @@ def framing_view(
         claim_functions(decoder.plan, {item.name for item in decoder.compared}, numbers)
     frames = _frames(senders, decoders)
     distinct = tuple({frame.decoder.name: frame for frame in frames.values()}.values())
-    message_frames = tuple(_message_frames(protocol, frames, decoders, views, names))
+    built = tuple(_message_frames(protocol, frames, decoders, views, names))
+    around = _several(item.frame.decoder.name for item in built if item.byte)
+    beside = _beside(built, around)
+    message_frames = tuple(replace(m, beside=beside[m.frame.decoder.name]) for m in built)
     algorithms = [item.checksum for decoder in decoders for item in decoder.checksums]
     streaming = tuple(dict.fromkeys(m.frame.decoder.name for m in message_frames if m.streams))
     puts = tuple(dict.fromkeys(item.view.put_function for item in message_frames if item.streams))
@@ -188,7 +195,8 @@ def framing_view(
         ),
         in_place=frozenset(frame.decoder.name for frame in distinct if frame.is_one_region)
         - {item.frame.decoder.name for item in message_frames if item.may_fill_group},
-        around_bytes=_several(item.frame.decoder.name for item in message_frames if item.byte),
+        around_bytes=around,
+        beside=beside,
         around_others=frozenset(i.frame.decoder.name for i in message_frames if not i.byte),
         trims=frozenset(item.frame.decoder.name for item in message_frames if item.is_trimmed),
         cuts_sent=any(item.streams and item.is_trimmed for item in message_frames),
@@ -200,6 +208,20 @@ def framing_view(
         texts=texts_of(protocol),
         helpers=helpers.texts[shared:],
     )
+
+
+def _beside(messages: Iterable[MessageFrame], around: frozenset[str]) -> dict[str, int]:
+    """What frames need beside the most for each byte of content, by name of the frame.
+
+    Several senders have one function that says it. What puts a frame around a byte takes any
+    identity.
+    """
+    found: dict[str, int] = {}
+    for message in messages:
+        name = message.frame.decoder.name
+        own = room_beside(message.decoder.plan, known=name not in around)
+        found[name] = max(found.get(name, own), own)
+    return found
 
 
 def _several(names: Iterable[str]) -> frozenset[str]:

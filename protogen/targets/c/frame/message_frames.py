@@ -10,6 +10,7 @@ import msgspec
 
 from protogen.c_language.numbers import hexadecimal
 from protogen.copying import replace
+from protogen.model.frame_room import room
 from protogen.model.identities import Runs
 from protogen.model.messages import Message, given_parts
 from protogen.model.parts import ChoicePart, IdentityPart, NumberPart
@@ -46,6 +47,8 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
     """True if its identity stands for payloads of one size."""
     is_cut_off: bool
     """True if a decoder counts the bytes of its frames, as some can be too long."""
+    beside: int = 0
+    """What frames of these senders need beside the most for each byte of content."""
 
     # --- the payload ------------------------------------------------------------------------------
 
@@ -79,7 +82,8 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
     @property
     def room(self) -> int:
         """Bytes of the buffer that suffice for every frame of the message."""
-        return self.decoder.plan.room(min(self.message.sizes.greatest, self.greatest_payload))
+        payload = min(self.message.sizes.greatest, self.greatest_payload)
+        return room(self.decoder.plan, payload, self.beside)
 
     @property
     def may_fill_group(self) -> bool:
