@@ -206,7 +206,58 @@ def named_parts(framing: str, names: list[str], folder: Path) -> str:
     decisions = DECISIONS if "accepted" in framing else ""
     path = folder / "demo.yaml"
     path.write_text(DEMO + decisions + framing.replace("PARTS", parts) + messages, encoding="utf-8")
+    file = write_sources(protocol_of_text(path), folder)
+    return "".join((folder / f"{file}.{kind}").read_text(encoding="utf-8") for kind in "hc")
+
+
+NUMBERED = """
+  m{index}:
+    id: {index}
+    from: host
+    fields:
+      {name}: {{type: uint8, range: [1, 40]}}
+      of_elements: {{type: uint16, range: [1, 5], count: {name}{formula}}}
+      of_others: {{type: sint16, range: [1, 5], count: 2}}
+"""
+
+
+@pytest.mark.parametrize("framing", ["zeros", "a length"])
+@pytest.mark.parametrize("formula", ["", " * 2"], ids=["at the end", "first"])
+def test_numbers_of_elements_may_be_called_like_any_variable_of_writers(
+    framing: str, formula: str, tmp_path: Path
+) -> None:
+    """Those of C and of C++; a compiler for either warns of a name that hides another one."""
+    text = numbered(framing, formula, ["plain", "plainer"], tmp_path)
+    words = {*VARIABLE.findall(text)} - {*DIRECTIVES, "of_elements", "of_others"}
+    words = sorted(word for word in words if not word.startswith("demo"))
+    assert {"value_0", "is_begun", "payload", "at"} < {*words}
+    numbered(framing, formula, words, tmp_path)
+    (tmp_path / "main.cpp").write_text('#include "demo.hpp"\n', encoding="utf-8")
+    for call in (["cc", *FLAGS, "demo.c"], ["c++", "-std=c++11", *FLAGS[1:], "main.cpp"]):
+        command = [require_tool(call[0]), *call[1:], "-fsyntax-only"]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stderr) == (0, "")
+
+
+def numbered(framing: str, formula: str, names: list[str], folder: Path) -> str:
+    """Headers and source of a message for each of these names of a number, which are written."""
+    messages = "".join(
+        NUMBERED.format(index=index, name=name, formula=formula) for index, name in enumerate(names)
+    )
+    decisions = DECISIONS if "accepted" in FRAMINGS[framing] else ""
+    frame = FRAMINGS[framing].replace("PARTS\n", "")
+    path = folder / "demo.yaml"
+    path.write_text(f"{DEMO}{decisions}{frame}\nmessages:{messages}", encoding="utf-8")
+    found = ""
+    for file in emit([protocol_of_text(path)], COptions(hpp=True)):
+        if file.path.suffix in (".c", ".h", ".hpp"):
+            (folder / file.path.name).write_bytes(file.bytes)
+            found += file.bytes.decode("utf-8")
+    return found
+
+
+def protocol_of_text(path: Path) -> Protocol:
+    """The protocol of a schema that may have been another one before."""
     protocol = compile_file(path).protocol
     assert protocol is not None
-    file = write_sources(protocol, folder)
-    return "".join((folder / f"{file}.{kind}").read_text(encoding="utf-8") for kind in "hc")
+    return protocol

@@ -704,9 +704,9 @@ static inline bool dagny_command_data_set_at(uint8_t *payload, size_t index, con
  * how many bytes the frame has; 0 where it wrote none, as the buffer is too short or something
  * can't be sent: `encode` says so of a field. A buffer of ..._FRAME_ROOM bytes always suffices; for
  * a shorter payload less does, but the buffer has to take the most that its bytes can need. `send`
- * hands the same bytes to a function, one after another, and needs no buffer. Where bytes of a
- * frame depend on those behind them, it has a copy of ..._FRAME_ROOM bytes on the stack, and
- * returns DAGNY_ERROR_RANGE where `frame` returns 0.
+ * hands the same bytes to a function, one after another, and needs no buffer. Where no byte can go
+ * before all are known, it makes the frame on the stack, in ..._FRAME_ROOM bytes, and returns
+ * DAGNY_ERROR_RANGE where `frame` returns 0.
  *
  * A message with a large array needs no struct: `begin` gives the place of the payload in a buffer
  * of ..._FRAME_ROOM bytes, with the defaults of all fields, or NULL where the buffer is shorter.

@@ -38,9 +38,9 @@ class Module(msgspec.Struct, frozen=True):
     spec_hash: str
     version: str | None
     made_by: str
+    """The version of protogen."""
     made_by_number: int
     """The same version as a number, which the preprocessor can compare."""
-    """The version of protogen."""
     baud: str | None
     idle_timeout_ms: str | None
     enums: tuple[EnumView, ...]

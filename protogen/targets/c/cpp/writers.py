@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import msgspec
 
 from protogen.c_language.numbers import integer_type
+from protogen.model.names import free_name
 from protogen.model.payload_plan import BytesStep, FloatStep, IntegerStep, RecordStep
 from protogen.model.types import Text
 from protogen.targets import naming
@@ -66,6 +67,11 @@ class CppWriter(msgspec.Struct, frozen=True):
     def end(self) -> str:
         """The call of C's function that ends it."""
         return call_of(self.item.called.end, self.item.end_arguments, {"frame": "frame_"})
+
+    @property
+    def is_begun(self) -> str:
+        """The variable of `end` for whether there is a frame to end; no parameter is called so."""
+        return free_name("is_begun", {item.split()[-1] for item in self.item.end_given})
 
 
 def cpp_writers(

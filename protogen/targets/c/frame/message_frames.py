@@ -202,7 +202,7 @@ class MessageFrame(msgspec.Struct, frozen=True, dict=True):
 
     @cached_property
     def streams(self) -> bool:
-        """True if each byte of the frame is known before those behind it."""
+        """True if each byte of the frame can go before those behind it are known."""
         return self.frame.plan.streams and not self.is_refused
 
     @property

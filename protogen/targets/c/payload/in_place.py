@@ -276,8 +276,9 @@ class _Writing:
         """The function that looks at fields whose default an encoder refuses."""
         lines = Lines()
         reading = self._first.reading(lines)
+        names = {it.name for it in self._amounts.values()}
         for number, place in enumerate(places):
-            step, name = place.step, f"value_{number}"
+            step, name = place.step, free_name(f"value_{number}", names)
             if isinstance(step, RepeatStep):
                 given = self._amounts.get(place.amount)
                 [count] = (
