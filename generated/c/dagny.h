@@ -39,7 +39,7 @@ extern "C" {
 #define DAGNY_SPEC_HASH "1d5a69e6f0daa3cc6de17b9b7bdfa067dee73b6a3f07294530412990adc6f795"
 /** Version of the protogen that made this file. */
 #define DAGNY_PROTOGEN_VERSION "0.1.0"
-/** The same for `#if`: 10,000 for each major version, 100 for each minor one. */
+/** The same for `#if`: 10,000 * major + 100 * minor + patch. */
 #define DAGNY_PROTOGEN_VERSION_NUMBER 100L
 /** Bits per second on the line. */
 #define DAGNY_BAUD 115200UL

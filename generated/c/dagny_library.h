@@ -39,7 +39,7 @@ extern "C" {
 #define DAGNY_LIBRARY_SPEC_HASH "a7092ead0b8db66d126ced8180d3166654ee1bcf3b0a0c7a4a08e8970ec47ae4"
 /** Version of the protogen that made this file. */
 #define DAGNY_LIBRARY_PROTOGEN_VERSION "0.1.0"
-/** The same for `#if`: 10,000 for each major version, 100 for each minor one. */
+/** The same for `#if`: 10,000 * major + 100 * minor + patch. */
 #define DAGNY_LIBRARY_PROTOGEN_VERSION_NUMBER 100L
 /** Bits per second on the line. */
 #define DAGNY_LIBRARY_BAUD 115200UL

@@ -38,7 +38,7 @@ extern "C" {
 #define MATTY_SPEC_HASH "cdb67c5317565b9738a484dc5d94d77752d0a1f43af67ee7e89c512ed9794d13"
 /** Version of the protogen that made this file. */
 #define MATTY_PROTOGEN_VERSION "0.1.0"
-/** The same for `#if`: 10,000 for each major version, 100 for each minor one. */
+/** The same for `#if`: 10,000 * major + 100 * minor + patch. */
 #define MATTY_PROTOGEN_VERSION_NUMBER 100L
 /** Bits per second on the line. */
 #define MATTY_BAUD 115200UL

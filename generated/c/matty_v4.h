@@ -37,7 +37,7 @@ extern "C" {
 #define MATTY_V4_SPEC_HASH "dceb8649d3dbb04ae2ad9f286946464ed2f6905f4664ab2a8cf2b210b638d828"
 /** Version of the protogen that made this file. */
 #define MATTY_V4_PROTOGEN_VERSION "0.1.0"
-/** The same for `#if`: 10,000 for each major version, 100 for each minor one. */
+/** The same for `#if`: 10,000 * major + 100 * minor + patch. */
 #define MATTY_V4_PROTOGEN_VERSION_NUMBER 100L
 /** Bits per second on the line. */
 #define MATTY_V4_BAUD 115200UL

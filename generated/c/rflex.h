@@ -39,7 +39,7 @@ extern "C" {
 #define RFLEX_SPEC_HASH "bdc0dbf75479fc3117451c2780def69871f73fedb48120ce349c7ab8d25414f4"
 /** Version of the protogen that made this file. */
 #define RFLEX_PROTOGEN_VERSION "0.1.0"
-/** The same for `#if`: 10,000 for each major version, 100 for each minor one. */
+/** The same for `#if`: 10,000 * major + 100 * minor + patch. */
 #define RFLEX_PROTOGEN_VERSION_NUMBER 100L
 /** Bits per second on the line. */
 #define RFLEX_BAUD 115200UL

@@ -39,7 +39,7 @@ extern "C" {
 #define RFLEX_DRIVERS_SPEC_HASH "6b293ff835f71a294248ac2f82f2aaa6e6ca9f1f9520933d977de3ead1d21d2d"
 /** Version of the protogen that made this file. */
 #define RFLEX_DRIVERS_PROTOGEN_VERSION "0.1.0"
-/** The same for `#if`: 10,000 for each major version, 100 for each minor one. */
+/** The same for `#if`: 10,000 * major + 100 * minor + patch. */
 #define RFLEX_DRIVERS_PROTOGEN_VERSION_NUMBER 100L
 /** Bits per second on the line. */
 #define RFLEX_DRIVERS_BAUD 115200UL

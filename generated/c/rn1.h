@@ -40,7 +40,7 @@ extern "C" {
 #define RN1_SPEC_HASH "52b96749db6c04ab62c29308f0a6a960c2ec0a24307e498c3bbbfb5cc9f6c2bc"
 /** Version of the protogen that made this file. */
 #define RN1_PROTOGEN_VERSION "0.1.0"
-/** The same for `#if`: 10,000 for each major version, 100 for each minor one. */
+/** The same for `#if`: 10,000 * major + 100 * minor + patch. */
 #define RN1_PROTOGEN_VERSION_NUMBER 100L
 /** Bits per second on the line. */
 #define RN1_BAUD 115200UL

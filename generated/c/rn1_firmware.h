@@ -40,7 +40,7 @@ extern "C" {
 #define RN1_FIRMWARE_SPEC_HASH "4c7afc95c9fa156c5677328201c53396e1fd4021ec0f97509bbf1a949aefe311"
 /** Version of the protogen that made this file. */
 #define RN1_FIRMWARE_PROTOGEN_VERSION "0.1.0"
-/** The same for `#if`: 10,000 for each major version, 100 for each minor one. */
+/** The same for `#if`: 10,000 * major + 100 * minor + patch. */
 #define RN1_FIRMWARE_PROTOGEN_VERSION_NUMBER 100L
 /** Bits per second on the line. */
 #define RN1_FIRMWARE_BAUD 115200UL

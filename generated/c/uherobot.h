@@ -38,7 +38,7 @@ extern "C" {
 #define UHEROBOT_SPEC_HASH "319850d58c204d8cbc2e7dde9a0ec863cee3d1caa80d06326176835ab5e5a4b4"
 /** Version of the protogen that made this file. */
 #define UHEROBOT_PROTOGEN_VERSION "0.1.0"
-/** The same for `#if`: 10,000 for each major version, 100 for each minor one. */
+/** The same for `#if`: 10,000 * major + 100 * minor + patch. */
 #define UHEROBOT_PROTOGEN_VERSION_NUMBER 100L
 
 /** What came of an encoder or a decoder. */

@@ -40,7 +40,7 @@ extern "C" {
 #define UHEROBOT_DAEMON_SPEC_HASH "8b7e96f33f6c769cdeb33f021dbf58a2505572a20e487dd7673d7bc09041d4a8"
 /** Version of the protogen that made this file. */
 #define UHEROBOT_DAEMON_PROTOGEN_VERSION "0.1.0"
-/** The same for `#if`: 10,000 for each major version, 100 for each minor one. */
+/** The same for `#if`: 10,000 * major + 100 * minor + patch. */
 #define UHEROBOT_DAEMON_PROTOGEN_VERSION_NUMBER 100L
 /** Bits per second on the line. */
 #define UHEROBOT_DAEMON_BAUD 57600UL
