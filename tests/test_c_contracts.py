@@ -59,6 +59,41 @@ def test_events_can_be_loaded_and_whole_frames_stay_in_their_buffer(
     assert proof.goals >= 80
 
 
+_TAKES_DECODER = re.compile(r"\b(\w+_decoder_\w+)\(\s*struct \w+_decoder \*")
+_HAS_CONTRACT = re.compile(r"^\*/\n[^;{}()]*\b(\w+)\(", re.MULTILINE)
+TAKEN_AS_GIVEN = {
+    # It calls the application's handler, which gets the event.
+    "messages": re.compile(r"_(?<!_decoder_)dispatch$"),
+    # EVA follows it: it writes nothing but the decoder.
+    "all": re.compile(r"_decoder_push$"),
+}
+"""Contracts that are relied upon, but not proved."""
+BY_EVA = {
+    "messages": re.compile(r"(?!)"),
+    "all": re.compile(r"_decoder_(?:init|push|flush)$"),
+}
+"""What changes a decoder without a contract that is proved."""
+
+
+@pytest.mark.parametrize("events", EVENTS)
+@pytest.mark.parametrize("path", PROVED, ids=name_of)
+def test_contracts_are_proved_of_all_that_changes_a_decoder(
+    path: Path, events: Events, tmp_path: Path
+) -> None:
+    """So that no contract is relied upon unproved, and none is left out."""
+    made = generate(protocol_of(path), tmp_path, COptions(events=events))
+    contracts = contracts_of(made)
+    text = contracts.header + contracts.source
+    proved = set(contracts.functions)
+    assert set(contracts.safe) <= proved
+    given = set(_HAS_CONTRACT.findall(text)) - proved
+    assert given == {name for name in given if TAKEN_AS_GIVEN[events].search(name)}
+    assert len(given) == len(made.protocol.senders)
+    changing = set(_TAKES_DECODER.findall(text))
+    assert {name for name in changing - proved if not BY_EVA[events].search(name)} == set()
+    assert len(changing) >= 4 * len(given)
+
+
 @pytest.mark.parametrize("path", PROVED, ids=name_of)
 def test_what_takes_payloads_is_the_same_for_all_events_and_for_messages(
     path: Path, tmp_path: Path
