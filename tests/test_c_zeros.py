@@ -1,9 +1,10 @@
 """A decoder in memory of zeros is one that was initialised, in every framing.
 
 Mostly `init` leaves zeros as they are. It depends on nothing but that memory and its arguments, so
-one run shows it. Where it sets more, all that can come of the two is looked through: any byte, or
-the end of the input, from each pair of states that they reach, until they are in one state. They
-report the same, and what follows is then the same for both.
+one run shows it. Where it sets more, all that can come of the two is looked through: any byte, the
+end of the input, or asking for what is left, from each pair of states that they reach, until they
+are in one state. They report the same, payloads included, and what follows is then the same for
+both.
 """
 
 from __future__ import annotations

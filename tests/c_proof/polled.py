@@ -233,7 +233,7 @@ class _Decoder:
                 made.loops(f"{prefix}_decoder_{name}", kept, assigns=["*decoder"])
 
     def begins(self) -> None:
-        """What starts at the beginning of an input, out of a decoder of any content, or of zeros."""
+        """What holds of a decoder that was initialised out of anything, and of one of zeros."""
         members = dict.fromkeys(_MEMBER.findall(self._between))
         zeros = " && ".join(f"zeros->{member} == 0" for member in members) or r"\true"
         holds = self._between.replace("decoder->", "zeros->")
