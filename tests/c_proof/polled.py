@@ -258,6 +258,8 @@ class _Decoder:
                 "assigns *event",
                 self._room,
                 f"ensures {self._event}",
+                f"ensures event->message != {self._none} ==>"
+                r" \valid_read(event->payload + (0 .. event->payload_size - 1))",
             )
         feed = f"{prefix}_decoder_feed"
         made.put_safe(
