@@ -33,7 +33,12 @@ def contracts_of(made: Generated) -> Contracts:
 
 
 def prove(
-    made: Generated, contracts: Contracts, only: tuple[str, ...] = (), *, patience: int = 60
+    made: Generated,
+    contracts: Contracts,
+    only: tuple[str, ...] = (),
+    *,
+    patience: int = 60,
+    named: str = "",
 ) -> Proof:
     """Prove the contracts of all functions, or of some; `patience` is for each goal, in seconds."""
     assert made.source is not None
@@ -41,7 +46,7 @@ def prove(
     made.source.write_text(contracts.source, encoding="utf-8")
     functions = only or contracts.functions
     return prove_contracts(
-        made.source, functions, made.folder, safe=contracts.safe, patience=patience
+        made.source, functions, made.folder, safe=contracts.safe, patience=patience, named=named
     )
 
 
@@ -57,6 +62,41 @@ def test_events_can_be_loaded_and_whole_frames_stay_in_their_buffer(
     proof = prove(made, contracts)
     assert proof.failed == ()
     assert proof.goals >= 80
+
+
+_TAKES_DECODER = re.compile(r"\b(\w+_decoder_\w+)\(\s*struct \w+_decoder \*")
+_HAS_CONTRACT = re.compile(r"^\*/\n[^;{}()]*\b(\w+)\(", re.MULTILINE)
+TAKEN_AS_GIVEN = {
+    # It calls the application's handler, which gets the event.
+    "messages": re.compile(r"_(?<!_decoder_)dispatch$"),
+    # EVA follows it: it writes nothing but the decoder.
+    "all": re.compile(r"_decoder_push$"),
+}
+"""Contracts that are relied upon, but not proved."""
+BY_EVA = {
+    "messages": re.compile(r"(?!)"),
+    "all": re.compile(r"_decoder_(?:init|push|flush)$"),
+}
+"""What changes a decoder without a contract that is proved."""
+
+
+@pytest.mark.parametrize("events", EVENTS)
+@pytest.mark.parametrize("path", PROVED, ids=name_of)
+def test_contracts_are_proved_of_all_that_changes_a_decoder(
+    path: Path, events: Events, tmp_path: Path
+) -> None:
+    """So that no contract is relied upon unproved, and none is left out."""
+    made = generate(protocol_of(path), tmp_path, COptions(events=events))
+    contracts = contracts_of(made)
+    text = contracts.header + contracts.source
+    proved = set(contracts.functions)
+    assert set(contracts.safe) <= proved
+    given = set(_HAS_CONTRACT.findall(text)) - proved
+    assert given == {name for name in given if TAKEN_AS_GIVEN[events].search(name)}
+    assert len(given) == len(made.protocol.senders)
+    changing = set(_TAKES_DECODER.findall(text))
+    assert {name for name in changing - proved if not BY_EVA[events].search(name)} == set()
+    assert len(changing) >= 4 * len(given)
 
 
 @pytest.mark.parametrize("path", PROVED, ids=name_of)
@@ -94,6 +134,49 @@ def test_contracts_are_comments(path: Path, events: Events, tmp_path: Path) -> N
         plain = re.sub(added, "", annotated, flags=re.MULTILINE)
         plain = re.sub(r"\w+_application\(", "decoder->handler(", plain)
         assert [*filter(str.strip, plain.splitlines())] == [*filter(str.strip, text.splitlines())]
+
+
+def never_ends(contracts: Contracts) -> list[str]:
+    """Add to each contract that asks for something: it never returns. Callers do not rely on it."""
+    asking = []
+    for name in contracts.functions:
+        head = re.compile(
+            rf"^(/\*@\n(?:(?!\*/).*\n)*?)\*/\n(?=[^;{{}}()]*\b{name}\()", re.MULTILINE
+        )
+        for part in ("header", "source"):
+            text = getattr(contracts, part)
+            found = head.search(text)
+            if found and " requires " in found[1]:
+                claim = f"{found[1]}    check ensures never: \\false;\n*/\n"
+                setattr(contracts, part, text[: found.start()] + claim + text[found.end() :])
+                asking.append(name)
+    return asking
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("events", EVENTS)
+@pytest.mark.parametrize("path", DOCUMENTS, ids=name_of)
+def test_contracts_do_not_contradict_themselves(path: Path, events: Events, tmp_path: Path) -> None:
+    """Where a contract, or one of a function that is called, cannot hold, all would be proved."""
+    made = generate(protocol_of(path), tmp_path, COptions(events=events))
+    contracts = contracts_of(made)
+    asking = never_ends(contracts)
+    assert sum(name.endswith("_decoder_feed") for name in asking) == len(made.protocol.senders)
+    proof = prove(made, contracts, tuple(asking), patience=1, named="never")
+    assert proof.goals == len(proof.failed) == len(asking)
+
+
+def test_a_contract_that_contradicts_itself_is_found(tmp_path: Path) -> None:
+    path = ROOT / "schemas" / "rn1.yaml"
+    made = generate(protocol_of(path), tmp_path, COptions(events="messages"))
+    contracts = contracts_of(made)
+    feed = "rn1_brain_decoder_feed"
+    never_ends(contracts)
+    before = contracts.source
+    contracts.source = before.replace("index <= size &&", "index < size && index > size &&")
+    assert contracts.source != before
+    proof = prove(made, contracts, (feed,), patience=10, named="never")
+    assert (proof.goals, proof.failed) == (1, ())
 
 
 # --- faults that have to be seen ------------------------------------------------------------------

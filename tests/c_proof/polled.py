@@ -17,6 +17,7 @@ _PAYLOAD_SIZE = re.compile(r"event->payload_size = ([^;]*);")
 _SHOWN = re.compile(r"_show\(decoder->buffer, (.*), event\);")
 _HEAD = re.compile(r"if \((content\[(\d+)\]) != ([^;{]*)\) \{")
 _PART = re.compile(r"(event->parts\.\w+) = (content\[\d+\]);")
+_MEMBER = re.compile(r"decoder->(\w+(?:\[\d+\])?)")
 _CHANGED = re.compile(r"(decoder->\w+) = (\w+);")
 _BEHIND_BUFFER = re.compile(r"decoder->buffer\[at - (\d)U\]")
 _LEAST = re.compile(r"_complete\(decoder->buffer, \(\w+\)\(at - (\d+)U\)")
@@ -232,12 +233,16 @@ class _Decoder:
                 made.loops(f"{prefix}_decoder_{name}", kept, assigns=["*decoder"])
 
     def begins(self) -> None:
-        """What starts at the beginning of an input, out of a decoder of any content."""
+        """What holds of a decoder that was initialised out of anything, and of one of zeros."""
+        members = dict.fromkeys(_MEMBER.findall(self._between))
+        zeros = " && ".join(f"zeros->{member} == 0" for member in members) or r"\true"
+        holds = self._between.replace("decoder->", "zeros->")
         self._put(
             "decoder_init",
             r"requires \valid(decoder)",
             "assigns *decoder",
             f"ensures {self._between}",
+            rf"ensures \forall struct {self._prefix}_decoder *zeros; {zeros} ==> {holds}",
         )
 
     def feeds(self) -> None:
@@ -253,6 +258,8 @@ class _Decoder:
                 "assigns *event",
                 self._room,
                 f"ensures {self._event}",
+                f"ensures event->message != {self._none} ==>"
+                r" \valid_read(event->payload + (0 .. event->payload_size - 1))",
             )
         feed = f"{prefix}_decoder_feed"
         made.put_safe(

@@ -48,11 +48,17 @@ class Proof:
 
 
 def prove_contracts(
-    source: Path, functions: Sequence[str], folder: Path, *, safe: Sequence[str], patience: int
+    source: Path,
+    functions: Sequence[str],
+    folder: Path,
+    *,
+    safe: Sequence[str],
+    patience: int,
+    named: str = "",
 ) -> Proof:
     """Prove the contracts of some functions of a file; and that safe ones do nothing undefined.
 
-    `patience` is for each goal, in seconds.
+    `patience` is for each goal, in seconds. Only clauses that are `named` so are proved, if any.
     """
     z3 = require_tool("z3")
     require_tool("why3")
@@ -62,7 +68,7 @@ def prove_contracts(
     config.write_text(_WHY3.format(z3=z3, version=version), encoding="utf-8")
     arguments = [*_READ, f"-cpp-extra-args=-I{folder}", f"-rte-select={','.join(safe)}"]
     arguments += [str(source), "-then", *_PROVE, f"-wp-timeout={patience}"]
-    arguments += [f"-wp-fct={','.join(functions)}"]
+    arguments += [f"-wp-fct={','.join(functions)}", *([f"-wp-prop={named}"] if named else [])]
     status, log = run_frama_c(arguments, WHY3CONFIG=str(config))
     assert status == 0, log[-4000:]
     [counts] = _GOALS.findall(log)
