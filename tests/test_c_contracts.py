@@ -9,6 +9,7 @@ with any that a contract allows.
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from compiled import DIALECTS, DOCUMENTS, ROOT, name_of, protocol_of
 
 from protogen.targets.c.options import COptions, Events
 
+ALL = bool(os.environ.get("PROTOGEN_PROVE_ALL"))
 EVENTS: tuple[Events, ...] = ("all", "messages")
 PROVED = (*DOCUMENTS, *DIALECTS)
 
@@ -153,9 +155,17 @@ def never_ends(contracts: Contracts) -> list[str]:
     return asking
 
 
+CONTRADICTIONS = [
+    (path, events)
+    for path in DOCUMENTS
+    for events in EVENTS
+    if ALL or (path.stem == "rn1" or (path.stem == "matty" and events == "messages"))
+]
+"""Where they are looked for: a prover has to give up on each goal, which takes half a minute."""
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("events", EVENTS)
-@pytest.mark.parametrize("path", DOCUMENTS, ids=name_of)
+@pytest.mark.parametrize(("path", "events"), CONTRADICTIONS, ids=name_of)
 def test_contracts_do_not_contradict_themselves(path: Path, events: Events, tmp_path: Path) -> None:
     """Where a contract, or one of a function that is called, cannot hold, all would be proved."""
     made = generate(protocol_of(path), tmp_path, COptions(events=events))
