@@ -10,6 +10,7 @@ from compiled import ROOT, protocol_of
 
 from protogen.model.frame_places import Place, Run, Side
 from protogen.model.frame_plan import EndRule, FramePlan, StartRule, Store
+from protogen.model.frame_room import room
 from protogen.model.parts import LiteralPart, PayloadPart
 from protogen.model.transparency import Base16, Escape, Substitution
 
@@ -80,7 +81,8 @@ def test_matty_counts_behind_its_length_and_may_be_as_large_again_when_escaped()
     assert (region.before, region.behind, region.longest) == (1, 0, 2)
     assert (region.literals_in_front, region.reaches_end) == (True, True)
     assert plan.size_known_at == 2
-    assert plan.room(3) == 2 * (4 + 3 + 1)
+    # Start, length (2 to 6) and command are none of these; counter, payload and sum can be.
+    assert room(plan, 3) == 3 + 2 * (1 + 3 + 1)
     assert [item.name for item in plan.shown] == ["counter", "command"]
 
 
@@ -113,7 +115,7 @@ def test_uherobot_counts_itself_and_travels_as_hex():
     assert plan.region is not None
     assert isinstance(plan.region.encoding, Base16)
     assert plan.region.parts == ("length", "type", "payload")
-    assert plan.room(1) == 2 * (3 + 1) + 1  # Content includes the literal in front; the end is 1.
+    assert room(plan, 1) == 1 + 2 * (2 + 1) + 1  # The literals in front and behind are one byte.
     assert plan.checksums == ()
 
 

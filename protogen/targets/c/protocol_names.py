@@ -26,9 +26,9 @@ ok error_size error_value error_encoding error_range error_space spec_hash versi
 implemented message unknown invalid no_message no_reason size value encoding noise checksum length
 stuffing truncated seeking taking failed lost found known open searching measuring empty needless
 before inside after frame stuffed fast_feed sse2 expect each has no_handlers no_weak api inline
-apart shared baud idle_timeout_ms protogen_version zeros names fine small_crc flash flash_8 flash_16
-flash_32 flash_64 counters count sum_failed wrong_sum other_frame packed as_in_memory hpp
-always_inline nodiscard
+apart shared baud idle_timeout_ms protogen_version protogen_version_number zeros names fine
+small_crc flash flash_8 flash_16 flash_32 flash_64 counters count sum_failed wrong_sum other_frame
+packed as_in_memory hpp always_inline nodiscard
 """
 _TAGS = "result message event_kind reason writer transmission counters"
 _TYPES = "put offer float64"
