@@ -33,7 +33,7 @@ _READ = (
 )
 """Without `switch`, WP follows where variables begin and end."""
 _PROVE = ("-wp", "-wp-cache=none", "-wp-par=4", "-wp-prover=z3")
-"""Four goals at once: WP looks now and then whether one is proved, which takes longer than most do."""
+"""Four goals at once: WP looks now and then whether one is proved, and most take less than that."""
 _GOALS = re.compile(r"Proved goals: +(\d+) / (\d+)")
 _GOAL = re.compile(r"Goal (\S+) : (?!Valid)")
 
