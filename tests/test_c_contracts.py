@@ -21,10 +21,9 @@ from c_proof.portable import portable
 from c_proof.wp import Proof, prove_contracts
 from compiled import DIALECTS, DOCUMENTS, ROOT, name_of, protocol_of
 
-from protogen.targets.c.options import COptions, Events
+from protogen.targets.c.options import EVENTS, COptions, Events
 
 ALL = bool(os.environ.get("PROTOGEN_PROVE_ALL"))
-EVENTS: tuple[Events, ...] = ("all", "messages")
 PROVED = (*DOCUMENTS, *DIALECTS)
 
 

@@ -12,10 +12,10 @@ from c_proof.others import others_driver
 from c_proof.reached import functions_of, reached
 from c_proof.sending import send_driver
 from compiled import DIALECTS, DOCUMENTS, name_of, protocol_of
-from test_c_contracts import EVENTS, contracts_of
+from test_c_contracts import contracts_of
 from test_c_proof import decode_driver_of
 
-from protogen.targets.c.options import COptions, Events
+from protogen.targets.c.options import EVENTS, COptions, Events
 
 LEFT = {
     "writers of frames, which are proved of other schemas": re.compile(

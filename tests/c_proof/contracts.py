@@ -96,6 +96,17 @@ class Contracts:
         self.source = self.source[: found.end()] + text + self.source[found.end() :]
 
 
+def identifies(made: Contracts, prefix: str, upper: str, *promises: str) -> None:
+    """What names the message of a frame: only where the payload fits it."""
+    made.put(
+        f"{prefix}_identify",
+        r"requires \valid(message) && \separated(message, parts, payload + (0 .. size - 1))",
+        "assigns *message",
+        rf"ensures \result == {upper}_FINE ==> holds(*message, payload, size)",
+        *promises,
+    )
+
+
 def room_of(made: Contracts, prefix: str) -> int:
     """Bytes in a decoder's buffer."""
     found = re.search(

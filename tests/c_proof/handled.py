@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from c_proof.contracts import Contracts, room_of
+from c_proof.contracts import Contracts, identifies, room_of
 from c_proof.whole import takes_whole
 
 _BEHIND = re.compile(r"&content\[(\d+)U? \+ decoder->payload\]")
@@ -17,12 +17,7 @@ static void {prefix}_application(void *user, const struct {prefix}_event *event)
 def handled(made: Contracts, prefix: str, upper: str) -> None:
     """What calls the application's handler, which is taken to leave the decoder as it is."""
     valid = r"requires \valid(decoder)"
-    made.put(
-        f"{prefix}_identify",
-        r"requires \valid(message) && \separated(message, parts, payload + (0 .. size - 1))",
-        "assigns *message",
-        rf"ensures \result == {upper}_FINE ==> holds(*message, payload, size)",
-    )
+    identifies(made, prefix, upper)
     made.put(f"{prefix}_invalid", valid, "assigns decoder->offset")
     if made.has(f"{prefix}_end_noise"):
         made.put(f"{prefix}_end_noise", valid, "assigns decoder->offset, decoder->noise")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 
-from c_proof.contracts import Contracts, room_of
+from c_proof.contracts import Contracts, identifies, room_of
 from c_proof.whole import takes_whole
 
 _PAYLOAD_AT = re.compile(r"event->payload = &content\[(\d+)\];")
@@ -52,6 +52,7 @@ class _Decoder:
         self._upper = upper
         self._none = f"{upper}_NO_MESSAGE"
         self._room = room_of(made, prefix)
+        self._limits = _LIMITS.findall(made.body(f"{prefix}_decoder_push"))
         [self._at] = _PAYLOAD_AT.findall(made.body(f"{prefix}_show"))
         [self._size] = _PAYLOAD_SIZE.findall(made.body(f"{prefix}_show"))
         self._last = max(map(int, _PLACE.findall(made.body(f"{prefix}_show"))))
@@ -69,11 +70,10 @@ class _Decoder:
             members = ("content", "limit", "count")
             bounds = [f"decoder->{member} <= {self._room}" for member in members]
             return " && ".join([*bounds, f"decoder->payload <= {self._most()}"])
-        limits = _LIMITS.findall(push)
-        if limits:
+        if self._limits:
             of_starts = " || ".join(
                 f"(decoder->buffer[0] == {start} && decoder->limit == {limit})"
-                for start, limit in limits
+                for start, limit in self._limits
             )
             return (
                 f"(decoder->limit == 0 || (1 <= decoder->content && decoder->content <="
@@ -120,9 +120,11 @@ class _Decoder:
         """What tells which message a frame is, of a decoder that looks at no more than one."""
         more = []
         made, prefix = self._made, self._prefix
-        limits = _LIMITS.findall(made.body(f"{prefix}_decoder_push"))
-        if limits:
-            sizes = (f"(content[0] == {start} && payload == {int(n) - 1})" for start, n in limits)
+        if self._limits:
+            sizes = (
+                f"(content[0] == {start} && payload == {int(limit) - 1})"
+                for start, limit in self._limits
+            )
             more = [f"requires {' || '.join(sizes)}"]
         for begin, size, less in _RUN.findall(made.body(f"{prefix}_complete")):
             last = f"{int(begin or 0) + int(size) - int(less or 0)} + payload - 1"
@@ -130,14 +132,15 @@ class _Decoder:
         told = self._payload.replace("decoder->buffer", "content")
         if told != self._payload:
             equal = _HEAD.findall(made.body(f"{prefix}_head_fits"))
-            places = [place for _, place, _ in equal]
+            last = max(int(place) for _, place, _ in equal)
+            head = rf"requires \valid_read(content + (0 .. {last}))"
             made.put_safe(
                 f"{prefix}_head_fits",
-                rf"requires \valid_read(content + (0 .. {max(map(int, places))}))",
+                head,
                 r"assigns \nothing",
                 *(rf"ensures \result ==> {left} == {right}" for left, _, right in equal),
             )
-            more.append(rf"requires \valid_read(content + (0 .. {max(map(int, places))}))")
+            more.append(head)
             of_message = rf"0 <= \result && \result < {self._none}"
             more.append(f"ensures {of_message} ==> payload == {told}")
         self._put(
@@ -150,13 +153,7 @@ class _Decoder:
     def judges(self) -> None:
         """Steps that return why a candidate is no frame, or that it is one."""
         made, prefix, upper = self._made, self._prefix, self._upper
-        self._put(
-            "identify",
-            r"requires \valid(message) && \separated(message, parts, payload + (0 .. size - 1))",
-            "assigns *message",
-            rf"ensures \result == {upper}_FINE ==> holds(*message, payload, size)",
-            rf"ensures \result != {upper}_FRAME",
-        )
+        identifies(made, prefix, upper, rf"ensures \result != {upper}_FRAME")
         kept = f"holds(decoder->message, decoder->buffer + {self._at}, decoder->payload)"
         frame = rf"\result == {upper}_FRAME"
         step = re.compile(
