@@ -7,7 +7,6 @@ number of bytes is safe.
 
 from __future__ import annotations
 
-import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +16,7 @@ from c_proof.bounded import Between, Harness, decode_harness, step_harness, whol
 from c_proof.esbmc import Verdict, check
 from c_proof.generated import Generated, generate
 from compiled import ROOT, protocol_of
+from tooling import PROVE_ALL
 
 SMALL = ROOT / "tests" / "c_proof"
 DECODES = [
@@ -83,8 +83,7 @@ STEPS = [
     Steps("bounded/counted_wire", "device", 15, COUNTED, "decoder->match <= decoder->next"),
 ]
 
-ALL = bool(os.environ.get("PROTOGEN_PROVE_ALL"))
-WHOLE = [("bounded/trimmed", 13), *[("bounded/escaped", 15)] * ALL]
+WHOLE = [("bounded/trimmed", 13), *[("bounded/escaped", 15)] * PROVE_ALL]
 """Frames taken whole: of payloads that are filled up, and stuffed ones: these take long."""
 
 

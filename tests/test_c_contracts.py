@@ -9,7 +9,6 @@ with any that a contract allows.
 
 from __future__ import annotations
 
-import os
 import re
 from pathlib import Path
 
@@ -20,10 +19,10 @@ from c_proof.generated import Generated, generate
 from c_proof.portable import portable
 from c_proof.wp import Proof, prove_contracts
 from compiled import DIALECTS, DOCUMENTS, ROOT, name_of, protocol_of
+from tooling import PROVE_ALL
 
 from protogen.targets.c.options import EVENTS, COptions, Events
 
-ALL = bool(os.environ.get("PROTOGEN_PROVE_ALL"))
 PROVED = (*DOCUMENTS, *DIALECTS)
 
 
@@ -158,7 +157,7 @@ CONTRADICTIONS = [
     (path, events)
     for path in DOCUMENTS
     for events in EVENTS
-    if ALL or (path.stem == "rn1" or (path.stem == "matty" and events == "messages"))
+    if PROVE_ALL or (path.stem == "rn1" or (path.stem == "matty" and events == "messages"))
 ]
 """Where they are looked for: a prover has to give up on each goal, which takes half a minute."""
 

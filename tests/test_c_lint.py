@@ -6,7 +6,6 @@ What the target deviates from is stated beside it: protogen/targets/c/.clang-tid
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 from collections.abc import Sequence
@@ -15,7 +14,7 @@ from pathlib import Path
 import pytest
 from c_proof.generated import Generated, generate
 from compiled import DOCUMENTS, FRAMINGS, ROOT, SCHEMAS, covering, name_of, protocol_of
-from tooling import require_tool
+from tooling import PROVE_ALL, require_tool
 
 from protogen.targets.c.options import EVENTS, STYLES, COptions, Events, Style
 
@@ -172,11 +171,7 @@ def test_the_style_is_the_one_that_is_shipped(
     quiet([require_tool("clang-format"), style_file, "--dry-run", "-Werror", *made.files, *stubs])
 
 
-DEPTH = (
-    ()
-    if os.environ.get("PROTOGEN_PROVE_ALL")
-    else ("-Xclang", "-analyzer-config", "-Xclang", "max-nodes=40000")
-)
+DEPTH = () if PROVE_ALL else ("-Xclang", "-analyzer-config", "-Xclang", "max-nodes=40000")
 """States in which the analyzer follows each function. Its default is 225,000, with which it takes
 several times as long; EVA, which gives up nowhere, goes through our schemas in test_c_proof.py."""
 

@@ -6,7 +6,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from pathlib import Path
 
@@ -28,12 +27,12 @@ from c_proof.needs import needs
 from c_proof.others import others_driver
 from c_proof.sending import filled, send_driver, unrolled
 from compiled import DIALECTS, DOCUMENTS, ROOT, SCHEMAS, name_of, protocol_of
+from tooling import PROVE_ALL
 
 from protogen.copying import replace
 from protogen.targets.c.options import EVENTS, COptions, Events
 
 WIDE, NARROW = MACHINES
-ALL = bool(os.environ.get("PROTOGEN_PROVE_ALL"))
 SLOW = ("dagny_library", "rflex_drivers")
 """Cases that take minutes: long arrays that fill payloads; some documents have them too."""
 SLOW_ALL = ("dagny",)
@@ -86,8 +85,8 @@ TOLD_BY_PARTS = ROOT / "tests" / "framings" / "part_fields_alone.yaml"
 DECODES = [
     (path, machine)
     for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS, TOLD_BY_PARTS)
-    for machine in MACHINES[: 1 + ALL]
-    if ALL or path.stem not in SLOW
+    for machine in MACHINES[: 1 + PROVE_ALL]
+    if PROVE_ALL or path.stem not in SLOW
 ]
 PUSHES: list[tuple[Path, Events, str]] = (
     [
@@ -96,7 +95,7 @@ PUSHES: list[tuple[Path, Events, str]] = (
         for events in EVENTS
         for machine in MACHINES
     ]
-    if ALL
+    if PROVE_ALL
     else [
         *((path, EVENTS[0], WIDE) for path in (*DOCUMENTS, *DIALECTS, *CONSTRUCTS, DIGITS, IDLE)),
         *((path, "messages", NARROW) for path in (*DOCUMENTS, *DIALECTS)),
@@ -241,7 +240,9 @@ def prove_sending(made: Generated, *, first: bool = False) -> Report:
     header, source = (path.read_text(encoding="utf-8") for path in (made.header, made.source))
     made.source.write_text(unrolled(source), encoding="utf-8")
     made.header.write_text(filled(header), encoding="utf-8")
-    return prove(made, send_driver(made.protocol, header, source, stuffs_great=ALL), first=first)
+    return prove(
+        made, send_driver(made.protocol, header, source, stuffs_great=PROVE_ALL), first=first
+    )
 
 
 def plain_driver(made: Generated, path: Path) -> Driver:
@@ -353,7 +354,7 @@ BEGUN = [
 BEGUN += [
     (path, machine)
     for path in (WRITTEN, NUMBERS_FIRST)
-    for machine in (MACHINES if ALL else MACHINES[:1])
+    for machine in (MACHINES if PROVE_ALL else MACHINES[:1])
 ]
 """Numbers of elements that vary take half a minute for each machine."""
 

@@ -12,6 +12,8 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
+PROVE_ALL = bool(os.environ.get("PROTOGEN_PROVE_ALL"))
+"""True if proofs are asked for that take minutes each."""
 STRICT = "PROTOGEN_REQUIRE_TOOLS"
 """Set this environment variable to make a missing tool fail a test instead of skipping it."""
 
